@@ -251,7 +251,7 @@ def _of_shell(motion: WallMotion, shell: int, segment: Segment, limits: dict[str
     if told:
         used = power(motion, shell)
         found["real_power"], found["apparent_power"] = float(np.abs(used.real).max()), float(used.apparent.max())
-        found["energy"] = float(np.trapezoid(used.real, dx=step))
+        found["energy"] = used.energy
     if law is not None and law.current_limit is not None:
         limits = {"current": law.current_limit, **limits}
     if law is not None and law.current_saturation and law.current_limit is not None:  # steps in which it begins to be held overshoot
@@ -280,7 +280,7 @@ def _of_segment(cut: OfSegments, asked: CutElectrode | None, number: int, thinne
         current=current,
         real_power=float(np.abs(real).max()),
         apparent_power=cut.width * given * current,
-        energy=float(np.trapezoid(real, dx=step)),
+        energy=float(cut.energy[number]),
     )
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from coaxshell.model.gains import law_of, saturates
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.differences import time_derivative
+from coaxshell.numerics.differences import time_derivative, work_along
 from coaxshell.response.energy.electrodes import on_segments
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import capacitances, strokes, volts_of
@@ -67,12 +67,18 @@ class OfSegments(NamedTuple):
         """Real power of each segment, W per metre of length, (N, T)."""
         return np.asarray(self.width * self.voltage * self.current)
 
+    @property
+    def energy(self) -> FloatArray:
+        """What the amplifier of each segment has given when the run ends, J per metre of length, (N,)."""
+        return self.width * work_along(self.voltage, self.charge)
+
 
 class Power(NamedTuple):
-    """Real and apparent power of one wall, each (T,): W and VA per metre of length."""
+    """Real and apparent power of one wall, each (T,): W and VA per metre of length; ``energy`` given when the run ends, J per metre."""
 
     real: FloatArray
     apparent: FloatArray
+    energy: float
 
 
 def electrical(motion: WallMotion, shell: int) -> Electrical:
@@ -193,7 +199,7 @@ def power(motion: WallMotion, shell: int) -> Power:
     problem = motion.solution.problem
     if (cut := of_segments(motion, shell)) is not None:
         rms = np.sqrt((cut.voltage**2).sum(axis=0) * (cut.current**2).sum(axis=0))
-        return Power(cut.power.sum(axis=0), cut.width * rms)
+        return Power(cut.power.sum(axis=0), cut.width * rms, float(cut.energy.sum()))
     found = electrical(motion, shell)
     circle = np.pi * np.where(np.arange(found.voltage.shape[1]) == 0, 2.0, 1.0)
     around = circle * problem.shells[shell].radius * problem.scales.length
@@ -202,7 +208,8 @@ def power(motion: WallMotion, shell: int) -> Power:
         return np.asarray(np.einsum("m,hmt,hmt->t", around, one, other), dtype=np.float64)
 
     u, i = found.voltage, found.current
-    return Power(over(u, i), np.sqrt(over(u, u) * over(i, i)))
+    energy = float(np.einsum("m,hm->", around, work_along(u, found.charge)))
+    return Power(over(u, i), np.sqrt(over(u, u) * over(i, i)), energy)
 
 
 def charge(motion: WallMotion, shell: int) -> FloatArray:

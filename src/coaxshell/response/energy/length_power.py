@@ -16,6 +16,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.differences import work_along
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.energy.electrodes import DrivenWall, driven_at
@@ -31,12 +32,12 @@ from coaxshell.structure.shell_model import ShellModel
 
 @dataclass(frozen=True)
 class LengthPower:
-    """Power of the amplifiers of one wall over time, W and VA, each (T,), and ``step``, s."""
+    """Power of the amplifiers of one wall over time, W and VA, each (T,), and ``energy``, what they have given by the end, J."""
 
     shell: int
     real: FloatArray
     apparent: FloatArray
-    step: float
+    energy: float
 
     @property
     def largest_real(self) -> float:
@@ -47,11 +48,6 @@ class LengthPower:
     def largest_apparent(self) -> float:
         """Largest apparent power."""
         return float(self.apparent.max())
-
-    @property
-    def energy(self) -> float:
-        """What was given by the end, J."""
-        return float(np.trapezoid(self.real, dx=self.step))
 
 
 def length_power(solution: SpatialSolution, progress: Progress | None = None) -> tuple[list[LengthPower], str]:
@@ -74,7 +70,7 @@ def length_power(solution: SpatialSolution, progress: Progress | None = None) ->
         raise InputError("whole_length", "no wall is driven between electrodes, whose charge is known", "leave it out")
     length = along_the_length(solution, progress)
     grid = length.grid
-    products = {i: np.zeros((3, grid.time.size)) for i in walls}
+    products, energies = {i: np.zeros((3, grid.time.size)) for i in walls}, dict.fromkeys(walls, 0.0)
     for j, wave in enumerate(wave_motions(problem, length.sampling, grid, length.forces)):
         motion = Motion(
             *(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, 1, wave.incident),
@@ -86,43 +82,50 @@ def length_power(solution: SpatialSolution, progress: Progress | None = None) ->
         for i in walls:
             wall = problem.shells[i]
             if isinstance(wall, ElasticWall):
-                products[i] += wave.length * _of_solids(motion, i, wall)
+                found, energy = _of_solids(motion, i, wall)
             else:
-                products[i] += _products(driven_at(motion, i, wall), grid, wave.length)
+                found, energy = _of_driven(driven_at(motion, i, wall), grid)
+            products[i] += wave.length * found
+            energies[i] += wave.length * energy
         if progress is not None:
             progress((j + 1.0) / length.count, f"axial wavenumber {j + 1:,} of {length.count:,}")
     scales, kept = problem.scales, slice(None, None, solution.settings.refinement)
-    watts = (scales.line_energy if length.uniform else scales.energy) / scales.time
-    step = solution.settings.time_step * scales.time
-    found = [LengthPower(i, watts * one[0, kept], watts * np.sqrt(one[1, kept] * one[2, kept]), step) for i, one in products.items()]
-    return found, "per metre of length" if length.uniform else "over the whole length"
+    unit = scales.line_energy if length.uniform else scales.energy
+    watts = unit / scales.time
+    each = [LengthPower(i, watts * ui[kept], watts * np.sqrt(uu * ii)[kept], unit * energies[i]) for i, (ui, uu, ii) in products.items()]
+    return each, "per metre of length" if length.uniform else "over the whole length"
 
 
-def _products(driven: DrivenWall, grid: LaplaceGrid, length: float) -> FloatArray:
-    """Return the integrals of u i, u^2 and i^2 over a wall in one wave, (3, T)."""
+def _of_driven(driven: DrivenWall, grid: LaplaceGrid) -> tuple[FloatArray, float]:
+    """Return the integrals of u i, u^2 and i^2 over a wall in one wave, (3, T), and the energy given, both per length."""
     strained = sum((one for one, _ in driven.charges), np.zeros_like(driven.volts))
     held = np.full((driven.weight.size, 1), sum(capacitance for _, capacitance in driven.charges))
-    return _over_circle(grid, length * driven.weight, driven.volts, strained, held, driven.charging)
+    return _over_circle(grid, driven.weight, driven.volts, strained, held, driven.charging)
 
 
 def _over_circle(
     grid: LaplaceGrid, weight: FloatArray, volts: ComplexArray, strained: ComplexArray, held: FloatArray, charging: ComplexArray
-) -> FloatArray:
-    """Return the integrals of u i, u^2 and i^2, (3, T), of the charge of strain and of what *charging* brings to capacitances *held*."""
+) -> tuple[FloatArray, float]:
+    """Return the integrals of u i, u^2 and i^2, (3, T), of the charge of strain and of what *charging* brings to capacitances *held*.
+
+    And the energy given by the end: the integral of u over the charge of strain, and what the capacitances hold.
+    """
 
     def over(one: FloatArray, other: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("m,hmt,hmt->t", weight, one, other))
 
     u, i = grid.invert(volts.copy()), grid.invert((strained + held * volts) * grid.nodes)
-    found = np.stack([over(u, i), over(u, u), over(i, i)])
-    if charging is volts:
-        return found
-    slow, fast = (grid.invert(held * one * grid.nodes) for one in (volts, charging))
-    field = grid.invert(charging.copy())
-    return found + np.stack([over(field, fast) - over(u, slow), over(field, field) - over(u, u), over(fast, fast) - over(slow, slow)])
+    found, field = np.stack([over(u, i), over(u, u), over(i, i)]), u
+    if charging is not volts:
+        slow, fast = (grid.invert(held * one * grid.nodes) for one in (volts, charging))
+        field = grid.invert(charging.copy())
+        found += np.stack([over(field, fast) - over(u, slow), over(field, field) - over(u, u), over(fast, fast) - over(slow, slow)])
+    stored = 0.5 * held[:, 0] * (field[..., -1] ** 2 - field[..., 0] ** 2)
+    given = work_along(u, grid.invert(strained.copy())) + stored
+    return found, float(np.einsum("m,hm->", weight, given))
 
 
-def _of_solids(motion: Motion, shell: int, wall: ElasticWall) -> FloatArray:
+def _of_solids(motion: Motion, shell: int, wall: ElasticWall) -> tuple[FloatArray, float]:
     """Return the same of an elastic wall per length, by the charge per radian that all of its actuators hold under one voltage."""
     volts, every, grid = volts_of(motion, shell), wall.transducers, motion.grid
     assert volts is not None
