@@ -65,7 +65,7 @@ def test_an_unstable_loop_grows_as_the_check_says(struck):
     grown = np.abs(model.w[0, growth.order])
     rate = np.log(grown[450:].max() / grown[350:400].max()) / 0.4
     assert rate == pytest.approx(growth.rate, rel=0.03)
-    with pytest.raises(InputError, match=r"control\.delay: 20\.00 µs makes .* order 2, 3 grows .* fastest order 3 by e\^\(14\.2 t\)"):
+    with pytest.raises(InputError, match=r"control\.delay: 20\.00 µs makes .* orders 2, 3 grow .* fastest order 3 by e\^\(14\.2 t\)"):
         cx.simulate(system, duration=2.0, time_step=0.01, modes=3)
 
 

@@ -172,7 +172,7 @@ class TestStability:
         assert (growth.order, growth.rate, growth.frequency) == pytest.approx((order, *root), rel=2e-8)
 
     def test_refused_with_orders_growth_frequency_and_what_to_change(self):
-        with pytest.raises(InputError, match=r"control\.derivative: 10 makes the closed loop unstable: order 7, 8, ") as caught:
+        with pytest.raises(InputError, match=r"control\.derivative: 10 makes the closed loop unstable: orders 7, 8, ") as caught:
             cx.simulate(electrodes(0, 10, "sensor", "actuator"), duration=4, modes=12)
         for part in ("fastest order 12 by e^(", "in transits, at ", "Hz", 'role = "self-sensing"', "positive gains stiffen and damp"):
             assert part in str(caught.value)

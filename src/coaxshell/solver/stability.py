@@ -314,15 +314,21 @@ def require_stable(problem: Problem, max_order: int, duration: float, shared: Sh
     fastest = fastest_growth(problem, unstable.orders, 1.0 / duration, wavenumber)
     names, said = _guilty(problem, max_order, duration, wavenumber)
     where = f" at the axial wavenumber {wavenumber:.3g}/a" if wavenumber else ""
-    listed = ", ".join(f"{order:.0f}" for order in unstable.orders[:5])
-    listed += f", ..., {unstable.orders[-1]:.0f} ({unstable.orders.size} in all)" if unstable.orders.size > 5 else ""
+    orders, grow = listed(unstable.orders)
     hertz = fastest.frequency / (2.0 * np.pi * problem.scales.time)
     told = f"order {fastest.order} by e^({rounded(fastest.rate, 3)} t), t in transits, at {engineering(hertz, 'Hz')}"
     raise InputError(
         " and ".join(names),
-        f"{said} makes the closed loop unstable: order {listed}{where} grows without bound, fastest {told}",
+        f"{said} makes the closed loop unstable: {orders}{where} {grow} without bound, fastest {told}",
         remedy(problem),
     )
+
+
+def listed(orders: FloatArray) -> tuple[str, str]:
+    """Return orders as they are told, the first five and the last, and the verb that goes with them."""
+    first = ", ".join(f"{order:.0f}" for order in orders[:5])
+    rest = f", ..., {orders[-1]:.0f} ({orders.size} in all)" if orders.size > 5 else ""
+    return (f"order {first}", "grows") if orders.size == 1 else (f"orders {first}{rest}", "grow")
 
 
 def _guilty(problem: Problem, max_order: int, duration: float, wavenumber: float) -> tuple[list[str], str]:

@@ -30,7 +30,7 @@ from coaxshell.solver.contour import NOWHERE, Bands, Contour, along_alone, fed_o
 from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import remedy
+from coaxshell.solver.stability import listed, remedy
 from coaxshell.solver.taking_bands import taking_bands
 from coaxshell.solver.tied import require_resolved
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
@@ -276,12 +276,12 @@ def require_stable_tie(problem: Problem, tied: Tied, duration: float) -> float:
     if laws[0].dead or tied.whole:
         where = f"{found.counts[0]:.0f} motions, of all orders together, grow without bound, the fastest"
     else:
-        listed = ", ".join(f"{one:.0f}" for one in found.patterns[:5])
-        listed += f", ..., {found.patterns[-1]:.0f} ({found.patterns.size} in all)" if found.patterns.size > 5 else ""
-        where = f"order {listed} of all shells together grows without bound, fastest order {fastest.pattern}"
+        orders, grow = listed(found.patterns)
+        where = f"{orders} of all shells together {grow} without bound, fastest order {fastest.pattern}"
         if cut is not None:
             others = ", ".join(map(str, sorted({cut - fastest.pattern, cut + fastest.pattern} - {fastest.pattern})))
-            where = f"order {listed}, with those that {cut} segments tie to it, grows without bound, fastest order "
+            them = "it" if found.patterns.size == 1 else "them"
+            where = f"{orders}, with those that {cut} segments tie to {them}, {grow} without bound, fastest order "
             where += f"{fastest.pattern} with {others}, ..."
     entries, value = _guilty(laws[0]) if len(laws) == 1 else ("control", "these laws together")
     told = f"by e^({rounded(fastest.rate, 3)} t), t in transits" + (f", at {engineering(hertz, 'Hz')}" if np.isfinite(hertz) else "")
