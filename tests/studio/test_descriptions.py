@@ -4,19 +4,40 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import threading
 
+import anyio
 import pytest
 from asking import described, solve
 
-from coaxshell.apps.studio import limits, links
+from coaxshell.apps.studio import limits, links, routes
 from coaxshell.errors import InputError
-from coaxshell.model import System, presets
+from coaxshell.model import System, presets, units
 
 
 def validated(client, **body):
     answer = client.post("/api/validate", json=body)
     assert answer.status_code == 200, answer.text
     return answer.json()
+
+
+def test_the_first_unusual_unit_is_read_beside_the_event_loop(monkeypatch):
+    """It takes half a second, in which the loop would answer nobody."""
+
+    def reader():
+        return anyio.run(routes.read, threading.get_ident, {})
+
+    monkeypatch.setattr(units, "knows_all", lambda: False)
+    assert reader() != threading.get_ident()
+    monkeypatch.setattr(units, "knows_all", lambda: True)
+    assert reader() == threading.get_ident()
+
+
+def test_units_tell_whether_one_is_left_that_takes_long():
+    units._registry.cache_clear()
+    assert not units.knows_all()
+    units.by_pint("furlong", "m")
+    assert units.knows_all()
 
 
 def test_the_schema_tells_units_limits_and_documentation(client):

@@ -193,6 +193,11 @@ def _unknown(text: str, unit: str, kind: Dimension) -> InputError:
     return InputError("", problem, hint(unit, known) + _remedy(kind))
 
 
+def knows_all() -> bool:
+    """Return whether no unit is left that takes long to read, as the first unusual one does."""
+    return _registry.cache_info().currsize > 0
+
+
 @lru_cache(maxsize=1)
 def _registry() -> Any:
     import pint

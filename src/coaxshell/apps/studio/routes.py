@@ -17,7 +17,7 @@ from coaxshell.apps.studio.downloads import described
 from coaxshell.apps.studio.refusals import RefusedError
 from coaxshell.apps.studio.state import Run, Studio
 from coaxshell.errors import InputError
-from coaxshell.model import System
+from coaxshell.model import System, units
 from coaxshell.solver.settings import Settings
 
 MOST_REVISION = 2**53
@@ -44,8 +44,11 @@ async def validate(request: Request) -> Response:
 
 
 async def read(work: Callable[[], T], data: dict[str, Any]) -> T:
-    """Return what is made of a description: here where it takes a millisecond, beside the event loop where it may take longer."""
-    return work() if len(str(data)) < bodies.LONG else await run_in_threadpool(work)
+    """Return what is made of a description: here where it takes a millisecond, beside the event loop where it may take longer.
+
+    As the first unusual unit does: half a second.
+    """
+    return work() if len(str(data)) < bodies.LONG and units.knows_all() else await run_in_threadpool(work)
 
 
 async def conversation(data: dict[str, Any], **more: Any) -> Response:
