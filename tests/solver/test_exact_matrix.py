@@ -72,7 +72,7 @@ def test_one_wall_senses_and_the_other_acts() -> None:
 def test_poles_and_margins_are_those_of_thin_walls() -> None:
     exact, thin = (cx.stability_margins(under(MIXED, (each, each)), duration=0.8, modes=3) for each in ("elastic", "thin"))
     np.testing.assert_allclose(exact.phase_margin.values, thin.phase_margin.values, atol=1.0)
-    with pytest.raises(cx.InputError, match=r"control\.matrix: .* makes .* of all shells together grows"):
+    with pytest.raises(cx.InputError, match=r"control\.matrix: .* makes .* of all shells together grow"):
         cx.simulate(under([[0.0, 1.0], [1.0, 0.0]]), **RUN)
 
 

@@ -218,5 +218,5 @@ def test_poles_are_those_of_waves() -> None:
     along = along_alone(problem, modes)
     here, near = (np.abs(determinants(along, along.open_loop, modes, x)[rates[0].pattern, 0]) for x in (s, s * (1 + 1e-4)))
     assert here < 1e-5 * near
-    with pytest.raises(cx.InputError, match=r"control\.matrix: .* makes the closed loop unstable.* of all shells together grows"):
+    with pytest.raises(cx.InputError, match=r"control\.matrix: .* makes the closed loop unstable.* of all shells together grow"):
         cx.simulate(pairs(BOTH, matrix=[[0.0, 1.0], [1.0, 0.0]]), stations=[0.0], **SMALL)
