@@ -33,7 +33,7 @@ help:
 	@echo "make pictures  the pictures of the pages anew, docs/figures, and the pages kept with their numbers: an hour and a half"
 	@echo "make studies   the searches and fronts of the design study anew, docs/studies/results: an hour"
 	@echo "make tables    what the package holds of slice and sphere, thin and exact walls, and the table of slips: a third of an hour"
-	@echo "make everything  every example, figure and table: demo, tables, studies, pictures, the paper, bench, docs; three hours"
+	@echo "make everything  every example, figure and table: demo, tables, studies, pictures, the paper, bench, docs; some hours"
 	@echo "make clean     remove the environment, caches and the demonstration"
 
 define ENVIRONMENT
