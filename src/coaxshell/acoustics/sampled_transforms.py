@@ -18,7 +18,7 @@ import numpy as np
 from scipy import fft
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.threads import WORKERS
 
 _MOMENTS = 14
 _FEW = 200_000

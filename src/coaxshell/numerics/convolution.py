@@ -12,7 +12,7 @@ import numpy as np
 from scipy import fft
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.threads import WORKERS
 
 _BY_MATRIX = 16
 """Steps up to which a product with the Toeplitz matrix is faster than FFTs."""

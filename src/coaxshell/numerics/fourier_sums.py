@@ -13,7 +13,8 @@ from scipy import fft, sparse
 from scipy.special import i0
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid, Nodes
+from coaxshell.numerics.laplace_grid import LaplaceGrid, Nodes
+from coaxshell.numerics.threads import WORKERS
 
 _OVERSAMPLING = 1.5
 _WIDTH = 14  # grid cells under the kernel; with the shape below the error is about 1e-11 of the largest sum

@@ -12,9 +12,7 @@ paper's bare case: outer head displacement 1.0e-5 with the sharp cut, 8e-8 with 
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Protocol
@@ -23,6 +21,7 @@ import numpy as np
 from scipy import fft
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.threads import WORKERS, map_on_threads
 
 WRAP_AROUND = 1e-10
 """e^{-sigma P}: damping of what wraps around the period; rounding is amplified by at most its inverse square root."""
@@ -34,23 +33,14 @@ FEWEST_SAMPLES = 512
 """Samples that a period has at least: what the band limit spreads from a front falls off with the number of steps only, and a short
 period brings the next front's share within reach of the end, where e^{sigma t} amplifies it."""
 
-WORKERS = min(os.cpu_count() or 1, 8)
-"""Threads for FFTs and for blocks of Laplace nodes."""
-
-
 _BLOCK = 2**17
 """Complex numbers that are inverted together, 2 MB: their histories have not left the processor's cache when they are weighted."""
 
 
 def in_blocks(work: Callable[[int], None], starts: range) -> None:
     """Do the work that begins at each of some numbers, on all threads where there are several."""
-    if len(starts) == 1 or WORKERS == 1:
-        for start in starts:
-            work(start)
-        return
-    with ThreadPoolExecutor(WORKERS) as pool:
-        for _ in pool.map(work, starts):
-            pass
+    for _ in map(work, starts) if len(starts) == 1 else map_on_threads(work, starts):
+        pass
 
 
 class Nodes(Protocol):

@@ -14,7 +14,8 @@ import numpy as np
 from scipy import fft
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.shell_model import FieldGain, Gain

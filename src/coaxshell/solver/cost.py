@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.faced_forces import PARTS
 from coaxshell.solver.interface.linear_many import POINTS
 from coaxshell.solver.run_size import COMPLEX, REAL, Size, size_of

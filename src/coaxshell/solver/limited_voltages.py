@@ -24,8 +24,9 @@ from scipy import fft
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import History, HistorySum, KernelTable
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.dimensions import limits_left_out
 from coaxshell.solver.electrode_loops import ElectrodeLoops, times
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.axial.blocks import BLOCK_NODES
 from coaxshell.solver.axial.faced import READ
 from coaxshell.solver.axial.limited_wave import axial_parities, even_about

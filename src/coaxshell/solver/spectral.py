@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
 import numpy as np
 
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.threads import map_on_threads
 
 # A block of complex numbers of this many order-node pairs is 1 MB, small enough that a dozen of them share a cache.
 _BLOCK_ELEMENTS = 64 * 1024
@@ -30,10 +30,9 @@ def node_blocks(grid: LaplaceGrid, max_order: int) -> list[slice]:
 
 def map_node_blocks(blocks: list[slice], work: Callable[[slice], None], progress: Progress | None, stage: str) -> None:
     """Run ``work`` on every block on all threads, telling the progress after each."""
-    with ThreadPoolExecutor(WORKERS) as pool:
-        for done, _ in enumerate(pool.map(work, blocks), start=1):
-            if progress is not None:
-                progress(done / len(blocks), stage)
+    for done, _ in enumerate(map_on_threads(work, blocks), start=1):
+        if progress is not None:
+            progress(done / len(blocks), stage)
 
 
 class Stopwatch:

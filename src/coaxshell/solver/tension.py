@@ -19,7 +19,8 @@ from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.operators import annulus
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.circle import circle_angles, on_circle
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.cavitation import AMBIENT, least_on_wall
 from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.scaling import Problem

@@ -12,7 +12,6 @@ either wall, with the sign (-1)^k between them; elsewhere it is J_m(xr) sin(phi)
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +22,7 @@ from coaxshell.acoustics.response_functions.echoes import CavityResponse
 from coaxshell.acoustics.response_functions.hankel import Phase, derivative_phase, expand, reach, rough_phase
 from coaxshell.acoustics.response_functions.sums import cheap_together, is_uniform, legs, levels, sines, snapped
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.threads import map_on_threads
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,9 +165,8 @@ def cavity(orders: npt.NDArray[np.int64], times: FloatArray, responses: Sequence
     result = np.empty((len(responses), orders.size, times.size))
     ranked = np.argsort(orders, kind="stable")
     blocks = [ranked[start : start + _BLOCK] for start in range(0, orders.size, _BLOCK)]
-    with ThreadPoolExecutor(WORKERS) as pool:
-        for block, values in zip(blocks, pool.map(lambda block: _block(orders[block], times, responses), blocks), strict=True):
-            result[:, block] = values
+    for block, values in zip(blocks, map_on_threads(lambda block: _block(orders[block], times, responses), blocks), strict=True):
+        result[:, block] = values
     for row, response in zip(result, responses, strict=True):
         drive = -response.inner if response.driven_inside else response.outer
         row[orders == 0] += 2.0 * drive * times / (response.outer**2 - response.inner**2)

@@ -32,9 +32,10 @@ from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.operators import annulus_amplitudes
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import ShareDone
 from coaxshell.numerics.radial_functions import RadialFunctions
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.response.energy.motion import Motion
 from coaxshell.solver.scaling import FluidRegion
 

@@ -12,15 +12,14 @@ energy of s tau/(1 + s tau) of the motion, and turns 2/tau of it per time into h
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple, Self
 
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
-from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.numerics.late import integrate
+from coaxshell.numerics.threads import map_on_threads
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import of_circuits, open_fields, volts_of
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
@@ -208,8 +207,8 @@ def _of_shapes(motion: Motion, piece: Piece, forces: ComplexArray, still: _AtRes
         return _of_amplitudes(motion, piece, part.squares[place], rows, amplitude, 0.5 * motion.circle[order])
 
     total = _Tally.none(motion)
-    with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
-        for one in pool.map(of_order, tasks):
+    with one_blas_thread():
+        for one in map_on_threads(of_order, tasks):
             total = total.plus(one)
     return total
 

@@ -7,13 +7,11 @@ the sum over their rows L^-1 Q x (:attr:`coaxshell.structure.elastic_basis.Order
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
-from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.threads import map_on_threads
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import driven_at, open_fields, volts_of
 from coaxshell.structure.elastic_basis import OrdersBasis
@@ -47,8 +45,8 @@ def solid_energy(motion: Motion, shell: int) -> WallEnergy:
             total += _of_parity(motion, part, place, forces)
         return np.asarray(weight * total)
 
-    with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
-        total = np.sum(list(pool.map(of_order, pairs)), axis=0)
+    with one_blas_thread():
+        total = np.sum(list(map_on_threads(of_order, pairs)), axis=0)
     found = WallEnergy(*total)
     return found if volts is None else found._replace(piezoelectric=found.piezoelectric + open_fields(motion, shell, volts))
 

@@ -18,9 +18,10 @@ from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
 from coaxshell.errors import InputError
 from coaxshell.model.gains import saturates
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.response.energy.balance import ARRAYS, labelled, whole_steps
 from coaxshell.response.energy.held_points import HeldPoints
 from coaxshell.response.energy.lines import WallsAtLines, lines_energy

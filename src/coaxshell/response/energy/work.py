@@ -18,7 +18,8 @@ from scipy import fft
 
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.response.energy.motion import Motion
 
 

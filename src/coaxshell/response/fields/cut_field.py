@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import NamedTuple, Protocol
 
@@ -12,7 +11,7 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.threads import WORKERS, map_on_threads
 from coaxshell.response.fields.axial_cut import PlaneField, VolumeField, axial_histories, lines_of, rings_of
 from coaxshell.response.fields.cross_cut import CircleField, RasterField, is_exact
 from coaxshell.response.fields.cuts import Cut
@@ -177,8 +176,7 @@ class CutField:
                         out[row][:, at] += z
 
         add(0)  # what a wave tabulates at first use is there before the threads start
-        with ThreadPoolExecutor(WORKERS) as pool:
-            list(pool.map(add, range(1, times.size)))
+        list(map_on_threads(add, range(1, times.size)))
 
 
 def cut_cost(waves: SpatialWaves, cut: Cut, radii: int, instants: int, quantities: int = 1) -> Cost:

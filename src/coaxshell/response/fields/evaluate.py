@@ -5,16 +5,15 @@ The scattered part is found by the cheaper of two ways, the incident one as it i
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.threads import map_on_threads
 from coaxshell.response.fields.grids import Grid, grid_of, labelled
 from coaxshell.response.fields.incident import Incident
 from coaxshell.response.fields.inversion import band
@@ -120,8 +119,7 @@ def add_incident(
             results[quantities.index("angular")][row, outside] += cos * across - sin * along
 
     add(0)  # what a wave tabulates at first use is there before the threads start
-    with ThreadPoolExecutor(WORKERS) as pool:
-        list(pool.map(add, range(1, times.size)))
+    list(map_on_threads(add, range(1, times.size)))
 
 
 LONG_NAMES = {

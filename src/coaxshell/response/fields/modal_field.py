@@ -15,7 +15,6 @@ without a division or a Bessel function but those of order 0 and 1; J_m from rat
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -27,7 +26,8 @@ from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.operators import annulus_amplitudes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.bessel_ratios import i_ratios
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.threads import WORKERS, map_on_threads
 from coaxshell.response.fields.inversion import Inversion
 from coaxshell.response.fields.request import Region
 from coaxshell.solver.excitation import incident_on_surface
@@ -294,8 +294,7 @@ class ModalField:
             for m, spectra in self.spectra(radii[span], quantity, inversion.weight):
                 result[span, :, m] = inversion(spectra).swapaxes(0, 1)
 
-        with ThreadPoolExecutor(WORKERS) as pool:
-            list(pool.map(work, range(0, radii.size, width)))
+        list(map_on_threads(work, range(0, radii.size, width)))
         return result
 
 

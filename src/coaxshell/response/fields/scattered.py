@@ -11,7 +11,6 @@ centre, where (-r, theta) is (r, theta + 180 degrees)), so that every stencil is
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -21,7 +20,8 @@ from scipy import fft, sparse
 from scipy.special import i0
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.threads import WORKERS, map_on_threads
 from coaxshell.response.fields.inversion import band, few_offsets
 from coaxshell.response.fields.modal_field import Quantity, modal_field
 from coaxshell.response.fields.request import FieldRequest, Region, Tell, mode_filter, reach, split
@@ -246,8 +246,7 @@ def to_points(
                 matrix = operator(raster, radius[blocks[i]], angle[blocks[i]], odd=odd)
             out[span, at[blocks[i]]] += (matrix @ field).T
 
-        with ThreadPoolExecutor(WORKERS) as pool:
-            list(pool.map(work, range(len(blocks))))
+        list(map_on_threads(work, range(len(blocks))))
 
 
 def raster_radii(problem: Problem, asked: FieldRequest, radius: FloatArray) -> int:

@@ -8,7 +8,6 @@ wavenumbers of the run alone make it take those, or are solved again where these
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -21,7 +20,8 @@ from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.threads import WORKERS, map_on_threads
 from coaxshell.response.fields.inversion import direct_matrix, window
 from coaxshell.response.fields.modal_field import Transfer, region_slopes
 from coaxshell.response.fields.request import SMEAR, FieldRequest, Region, Tell, filter_weight
@@ -238,8 +238,7 @@ def each_block(waves: SpatialWaves, radii: int, work: Callable[[slice], Found], 
     count = waves.grid.nodes.size
     edges = np.linspace(0, count, max(1, -(-count // waves.block_size(radii))) + 1).astype(int)
     blocks = [slice(int(a), int(b)) for a, b in pairwise(edges)]
-    small = one_blas_thread() if waves.problem.two_faced else nullcontext()  # products of elastic walls' shapes
-    with small, ThreadPoolExecutor(WORKERS) as pool:
-        for done, found in enumerate(pool.map(work, blocks), start=1):
+    with one_blas_thread() if waves.problem.two_faced else nullcontext():  # products of elastic walls' shapes
+        for done, found in enumerate(map_on_threads(work, blocks), start=1):
             tell(done / len(blocks))
             yield found

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import fft
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.structure_spectra import StructureSpectra
 

@@ -20,8 +20,9 @@ from scipy import fft
 
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.adjoint.answer import Backwards, Felt
 from coaxshell.solver.adjoint.planes import of_planes
 from coaxshell.solver.coupling import fluid_matrix

@@ -17,8 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.numerics.blas_threads import one_blas_thread
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, ShareDone, heard_by
+from coaxshell.numerics.threads import WORKERS
 
 BLOCK_NODES = 600
 """Nodes of a block: NumPy lets other threads run only beside its loops of more than 500 numbers, and those over nodes are the shortest."""

@@ -10,14 +10,14 @@ them; :mod:`coaxshell.solver.axial.tied_faces` closes the loops.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.blas_threads import one_blas_thread
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.threads import map_on_threads
 from coaxshell.solver.axial.families import Family, outside_loads
 from coaxshell.solver.cascade import CascadeSystem, FaceMotion
 from coaxshell.solver.scaling import Problem
@@ -158,5 +158,5 @@ def make_shapes(problem: Problem, modes: Sequence[Modes]) -> None:
     solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
     pairs = [(wall, one) for one in modes for wall in solids]
     if pairs:
-        with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:  # many small matrices
-            list(pool.map(lambda pair: pair[0].prepare_stations(pair[1]), pairs))
+        with one_blas_thread():  # many small matrices
+            list(map_on_threads(lambda pair: pair[0].prepare_stations(pair[1]), pairs))

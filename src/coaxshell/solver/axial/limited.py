@@ -23,8 +23,9 @@ from scipy import fft
 
 from coaxshell.model.gains import limits_currents
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.axial.blocks import BLOCK_NODES, BlockMap, node_blocks, on_threads
 from coaxshell.solver.axial.lack import Channels, VoltageLack, lack_of, wave_patterns
 from coaxshell.solver.axial.limited_surface import SurfaceStep, WallSurface

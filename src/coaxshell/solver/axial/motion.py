@@ -14,7 +14,6 @@ they are two more parities, of the axis, which share all operators. Forces of po
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,8 +21,9 @@ import numpy as np
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.threads import map_on_threads
 from coaxshell.solver.axial.belts import charged, driven_sets
 from coaxshell.solver.axial.faced import make_shapes
 from coaxshell.solver.axial.faced_motion import motions_and_faces
@@ -149,8 +149,8 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
             return _superposed(shares, [amplitude[:rows] for amplitude in found], around)
 
         make_shapes(problem, [modes])
-        with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
-            motion = np.concatenate(list(pool.map(work, range(len(blocks)))), axis=-1)
+        with one_blas_thread():
+            motion = np.concatenate(list(map_on_threads(work, range(len(blocks)))), axis=-1)
         length = (sampling.period if spherical else 1.0) * (1.0 if modes.two_dimensional else 0.5) if waves.modes is sampling.modes else 1.0
         if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
             motion, shares = motion[:, :, :around], shares[:, :1]  # forces in pairs about z = 0 make nothing odd

@@ -14,8 +14,9 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.threads import WORKERS
 from coaxshell.solver.axial.belts import driven_sets
 from coaxshell.solver.axial.blocks import node_blocks
 from coaxshell.solver.axial.faced import make_shapes

@@ -111,7 +111,7 @@ def block_response(links: LinkConstants, kernels: FloatArray, imposed: FloatArra
     unit = np.concatenate([np.eye(points), np.zeros((points, further))], axis=1)
     carry = np.where(links.inertia > 0, 1.0, 0.0)[:, None]
     for lag in range(lags):
-        excited = sum((kernels[k] @ found.force[lag - k] for k in range(1, lag + 1)), np.zeros((*systems, points, columns)))
+        excited = (kernels[1 : lag + 1] @ found.force[:lag][::-1]).sum(axis=0)
         excited[..., points:] += imposed[lag]
         known_w, known_q = w + half * v, q + half * u
         law = stiffness * (pairs @ known_q - known_w) - tangent * excited
