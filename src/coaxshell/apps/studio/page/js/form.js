@@ -108,7 +108,7 @@ const WAVES = {
 function dimensions(value) {
   const select = el("select", { id: "at-resolution.dimensions", "data-path": "resolution.dimensions", onchange: () => change("resolution.dimensions", Number(select.value)) },
     ...[[2, "two: alike along the axis"], [3, "three: at stations"]].map(([number, text]) => costed(`dimensions/${number}`, number, text, number === (space ? 3 : 2))));
-  const choice = el("div", { class: "choice" }, el("label", { for: select.id }, "Dimensions"), select);
+  const choice = el("div", { class: "choice long" }, el("label", { for: select.id }, "Dimensions"), select);
   if (!space) return group("dimensions", "Dimensions", false, digest(value), choice, el("p", { class: "hint", id: "cost" }, costText(costs)));
   const stations = leaf({ long: true, type: "string", list: true, description: "Axial positions at which the shells answer, such as 0, 70 cm" }, "resolution.stations", "stations", [value.stations ?? 0].flat().join(", "));
   return group("dimensions", "Dimensions", true, digest(value), choice, stations, el("p", { class: "hint" }, `At most ${world.limits.stations}, in m or as text, with commas between: 0, 0.25, 70 cm.`),
@@ -338,7 +338,7 @@ function leaf(schema, path, name, value) {
   }
   if (schema.enum) {
     const select = el("select", { ...shared, onchange: () => change(path, select.value) }, ...schema.enum.map((one) => (name === "theory" ? costed(`theory/${path.match(/\d+/)}/${one}`, one, one, one === value) : el("option", { value: one, selected: one === value }, one))));
-    return el("div", { class: "field" }, text, select);
+    return el("div", { class: name === "theory" ? "field broad" : "field" }, text, select);
   }
   if (schema.type === "boolean") {
     const box = el("input", { ...shared, type: "checkbox", checked: Boolean(value ?? schema.default), onchange: () => change(path, box.checked) });
