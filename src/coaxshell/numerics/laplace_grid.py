@@ -135,8 +135,9 @@ class LaplaceGrid:
         """
         window = self.taper() if window is None else window
         growth = np.exp(self.shift * self.time) / self.time_step
-        width, stop = max(1, _BLOCK // self.nodes.size), self.steps + 1
-        rows = spectrum.reshape(-1, self.nodes.size)
+        rows, stop = spectrum.reshape(-1, self.nodes.size), self.steps + 1
+        blocks = max(1, -(-rows.size // _BLOCK))
+        width = max(1, -(-len(rows) // blocks))
         result = np.empty((len(rows), stop))
 
         def invert_some(first: int) -> None:

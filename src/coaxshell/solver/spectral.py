@@ -23,7 +23,7 @@ def node_blocks(grid: LaplaceGrid, max_order: int) -> list[slice]:
     """Return consecutive slices of the Laplace nodes, each of about the same size."""
     count = grid.nodes.size
     width = max(64, _BLOCK_ELEMENTS // (max_order + 1))
-    blocks = max(1, round(count / width))
+    blocks = max(min(2, count // 64), round(count / width), 1)  # of short runs two, that two threads have something to do
     edges = np.linspace(0, count, blocks + 1).astype(int)
     return [slice(int(a), int(b)) for a, b in pairwise(edges)]
 

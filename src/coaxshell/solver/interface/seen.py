@@ -21,6 +21,7 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.convolution import KernelTable
+from coaxshell.numerics.threads import map_on_threads
 from coaxshell.solver.faced_forces import combined_march_weights
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
 from coaxshell.solver.interface.lattice import channels, folding
@@ -70,10 +71,12 @@ class SeenStructure(StructureSpectra):
         if problem.two_faced:
             return self._faced_weights({(i, j): shares(i, j) for i, j in pairs})
         late = unresolved_orders(problem, grid, whole.modes)
-        found = {
-            (i, j): combined_velocity_weights(problem, grid, whole.compliance[i, j], (i, j), np.where(late, 0.0, shares(i, j)))
-            for i, j in pairs
-        }
+        compliance = whole.compliance
+
+        def combined(pair: tuple[int, int]) -> FloatArray:
+            return combined_velocity_weights(problem, grid, compliance[pair], pair, np.where(late, 0.0, shares(*pair)))
+
+        found = dict(zip(pairs, map_on_threads(combined, pairs), strict=True))
         if late.any():
             late_weights, _ = trapezoidal_weights(problem, grid, Modes(whole.modes.orders[late]), [])
             for i, j in pairs:
