@@ -28,7 +28,7 @@ def little_damping_does_nothing(runs: Runs) -> Finding:
     changes = {c: stress_changes(found[c], found[0.0]) for c in (1e4, 1e5)}
     worst = max(max(of.values()) for of in changes.values())
     measured = {f"c = {c:g}, {name}": v for c, of in changes.items() for name, v in named(of, "change (%)").items()}
-    why = "The stress changes by " + "; ".join(f"{sentence(of)} with {c:g}" for c, of in changes.items()) + "."
+    why = "The stress changes by " + "; ".join(f"{sentence(of)} with {c:.0e} N s/m" for c, of in changes.items()) + "."
     return Finding(measured, graded(worst <= 0.05, worst <= 0.15), why)
 
 
