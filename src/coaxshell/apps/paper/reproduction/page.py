@@ -26,7 +26,8 @@ _STYLE = """
 .part { color: var(--part); } code { font-size: .86em; background: var(--wash); padding: .1em .35em; border-radius: .25em; }
 td:nth-child(7) { white-space: normal; } td .dim { font-size: .95em; }
 .claims th, .slips th { white-space: normal; vertical-align: bottom; }
-@media (min-width: 60.01rem) { .claims td:nth-child(n + 4):nth-child(-n + 7) { width: 4.6rem; } .claims td:nth-child(3) { width: 28%; } .claims td:nth-child(8) { width: 30%; }
+@media (min-width: 60.01rem) { .claims td:nth-child(n + 4):nth-child(-n + 7) { width: 4.6rem; }
+  .claims td:nth-child(3) { width: 28%; } .claims td:nth-child(8) { width: 30%; }
   .claims.both td:nth-child(n + 3):nth-child(-n + 4) { width: 5.2rem; }
   .claims.both td:nth-child(n + 5):nth-child(-n + 6) { width: 33%; white-space: normal; } }
 video { width: 100%; max-width: 66rem; border: 1px solid var(--line); border-radius: .4rem; }
