@@ -30,8 +30,8 @@ help:
 	@echo "make types     static types"
 	@echo "make bench     time, memory and cost curves of the solver"
 	@echo "make docs      the documentation as a site, docs/built/index.html, every example run"
-	@echo "make pictures  the pictures of the pages anew, docs/figures, and the pages kept with their numbers: an hour and a half"
-	@echo "make studies   the searches and fronts of the design study anew, docs/studies/results: an hour"
+	@echo "make pictures  the pictures of the pages anew, docs/figures, and the pages kept with their numbers: three quarters of an hour"
+	@echo "make studies   the searches and fronts of the design study anew with their pictures, docs/studies/results: an hour"
 	@echo "make tables    what the package holds of slice and sphere, thin and exact walls, and the table of slips: a third of an hour"
 	@echo "make everything  every example, figure and table: demo, tables, studies, pictures, the paper, bench, docs; some hours"
 	@echo "make clean     remove the environment, caches and the demonstration"
@@ -132,7 +132,8 @@ docs: $(STAMP_DOCS) chromium
 	@$(BIN)/python -m pytest -q -n 2 --dist loadfile -m "$(DOCS_CHECKS)" docs/checks
 	@echo "open docs/built/index.html"
 
-# What the pages show that is not made at every build: `make docs` runs the examples and writes reports and tables itself.
+# What the pages show that is not made at every build: `make docs` runs the examples and writes reports and tables itself, `make studies`
+# the pictures of its searches.
 pictures: export OPENBLAS_NUM_THREADS = 1
 pictures: $(STAMP) chromium
 	@$(BIN)/python docs/pictures

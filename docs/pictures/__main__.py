@@ -36,16 +36,12 @@ RECIPES: dict[str, Recipe] = {
     "identify.png": of_runs.identify,
     "control-limits.png": of_control.limits,
     "control-segments.png": of_control.segments,
-    "design-study-a.png": of_studies.equal,
-    "design-study-b.png": of_studies.mirror,
-    "design-study-c.png": of_studies.hybrid,
-    "design-study-d.png": of_studies.front,
     "design-study-optima.png": of_studies.optima,
     "studio.png": of_studio.home,
     "studio-space.png": of_studio.space,
     "studio-designs.png": of_studio.designs,
 }
-"""Every picture in docs/figures, and what makes it."""
+"""The pictures in docs/figures, but those of searches, which docs/studies draws as it carries them out; and what makes each."""
 PAGES: dict[str, Recipe] = {"conformance.md": of_conformance.write, "statements.md": of_statements.write}
 """Pages in docs whose numbers take too long for every build."""
 

@@ -39,13 +39,6 @@ def save_beside(figures: Sequence[Any], target: Path, width: int) -> None:
     sheet.save(target, optimize=True)
 
 
-def lighten(picture: Path, shades: int) -> None:
-    """Write a picture that stands in a file again, with so many bits of each colour."""
-    with Image.open(picture) as image:
-        fewer = _fewer_shades(image.convert("RGB"), shades)
-    fewer.save(picture, optimize=True)
-
-
 def _drawn(figure: Any, dpi: float) -> Image.Image:
     drawn = BytesIO()
     figure.savefig(drawn, format="png", dpi=dpi)

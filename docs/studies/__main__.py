@@ -1,5 +1,7 @@
 """Carry the design study out anew: every search, trial and front of its page; all or those named.
 
+The pictures of how a search went are drawn with it, for they show every design tried.
+
 Run: python docs/studies [--into FOLDER] [NAME ...], or make studies
 """
 
@@ -17,21 +19,33 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from PIL import Image
+
 HERE = Path(__file__).resolve().parent
 SEARCHES = ("a-equal-absorbers", "b-mirror-pairs", "b-25-free", "b-60-free", "c-hybrid", "d-mass-front", "e-robust-free")
 """Study files of the same name, in an order in which each finds what it begins from."""
 SCRIPTS = {"c-electrodes": "c_electrodes.py", "d-front": "d_front.py", "optima-in-space": "optima_in_space.py"}
 """What no study file can say, and the script that does it from the results of b."""
+PICTURES = {
+    "a-equal-absorbers": "design-study-a.png",
+    "b-mirror-pairs": "design-study-b.png",
+    "c-hybrid": "design-study-c.png",
+    "d-mass-front": "design-study-d.png",
+}
+"""Searches that the page shows, and the picture of each in docs/figures."""
 OWN_FILE = {"optima-in-space": "peaks.csv"}
 """Scripts that write a file of this name instead of a folder."""
 
 
-def search(name: str, target: Path) -> None:
+def search(name: str, target: Path, picture: Path | None) -> None:
     """Search as a study file says, and keep what the page needs of it."""
     with TemporaryDirectory() as folder:
-        words = ["optimise", HERE / f"{name}.toml", "--output", "found", "--quiet"]
+        words = ["optimise", HERE / f"{name}.toml", "--output", "found", "--quiet", *(["--figure", "found.png"] if picture else [])]
         subprocess.run([sys.executable, "-m", "coaxshell", *words], check=True, stdout=subprocess.DEVNULL, cwd=folder)  # its journal too
         keep(Path(folder) / "found", target)
+        if picture:
+            with Image.open(Path(folder) / "found.png") as drawn:  # many thin lines make a file that pages would load slowly
+                drawn.convert("RGB").quantize(128, dither=Image.Dither.NONE).save(picture, optimize=True)
 
 
 def keep(found: Path, target: Path) -> None:
@@ -71,10 +85,10 @@ def _write(path: Path, rows: Sequence[Sequence[object]]) -> None:
         csv.writer(file, lineterminator="\n").writerows(rows)
 
 
-def carry_out(name: str, target: Path) -> None:
+def carry_out(name: str, target: Path, pictures: Path) -> None:
     """Carry out one of them, into a folder that is there."""
     if name in SEARCHES:
-        search(name, target)
+        search(name, target, pictures / PICTURES[name] if name in PICTURES else None)
         return
     own = target / OWN_FILE[name] if name in OWN_FILE else target
     if own.is_file():
@@ -87,16 +101,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python docs/studies", description=__doc__)
     known = (*SEARCHES, *SCRIPTS)
     parser.add_argument("names", nargs="*", metavar="NAME", help="folders in docs/studies/results; all unless given")
-    parser.add_argument("--into", type=Path, metavar="FOLDER", default=HERE / "results", help="instead of docs/studies/results")
+    parser.add_argument("--into", type=Path, metavar="FOLDER", help="instead of docs/studies/results and docs/figures")
     asked = parser.parse_args(arguments)
     unknown = set(asked.names) - set(known)
     if unknown:
         parser.error(f"there is no {', '.join(sorted(unknown))}; there are {', '.join(known)}")
     for name in asked.names or known:
         begun = time.perf_counter()
-        target = asked.into / name
+        target = (asked.into or HERE / "results") / name
         target.mkdir(parents=True, exist_ok=True)
-        carry_out(name, target)
+        carry_out(name, target, asked.into or HERE.parent / "figures")
         sys.stdout.write(f"{name}  {time.perf_counter() - begun:.0f} s\n")
         sys.stdout.flush()
 
