@@ -115,6 +115,7 @@ def test_a_system_is_built_from_nothing_by_keyboard(opened):
     until(page, f"{SYSTEM}.shells[1].layers[1].thickness === 0.001")
     page.get_by_role("button", name="Move Layer 2 inwards").press("Enter")
     until(page, f"{SYSTEM}.shells[1].layers[0].thickness === 0.001")
+    until(page, "document.activeElement.closest('[data-group]').dataset.group === 'shells[1].layers[0]'")  # the form is made anew
     page.locator('[data-act="shells[1]:in"]').press("Enter")
     until(page, "document.activeElement.closest('[data-group]').dataset.group === 'shells[0]'")
     assert held(page, f"{SYSTEM}.shells.map(({{radius, layers}}) => [radius, layers.length])") == [[0.5, 2], [0.625, 1]]
