@@ -121,11 +121,11 @@ def test_a_system_is_built_from_nothing_by_keyboard(opened):
     assert held(page, f"{SYSTEM}.shells.map(({{radius, layers}}) => [radius, layers.length])") == [[0.5, 2], [0.625, 1]]
     for count in (1, 2):
         page.locator("#section").get_by_role("button", name="Add absorber").press("Enter")
-        until(page, f"{SYSTEM}.absorbers.length === {count}")
+        until(page, f"{SYSTEM}.absorbers.length === {count} && document.querySelectorAll('[role=slider]').length === {count + 1}")
     assert held(page, ABSORBERS) == [0, 180]
     page.locator('details[data-group="source"] > summary').press("Enter")
     page.locator('select[id="kind-source"]').select_option(label="Several, one by one")
-    until(page, f"Array.isArray({SYSTEM}.source)")
+    until(page, f"Array.isArray({SYSTEM}.source) && document.querySelector('[data-group=\"source[0]\"]') !== null")
     page.get_by_role("button", name="Add source").press("Enter")
     until(page, f"{SYSTEM}.source.length === 2")
     until(page, "window.coaxshell.state.runs.current.shells.length === 2 && !window.coaxshell.state.problems.length")
